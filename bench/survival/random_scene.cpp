@@ -149,6 +149,7 @@ class RandomScene {
     model["width"] = 1 + late_.below(3);
     model["substeps"] = 1 + late_.below(8);
     if (late_.chance(0.5)) model["goals"] = "extrapolated";
+    if (Dice(number_ ^ 0x4cf5ad43).chance(0.4)) model.update({{"substeps", "auto"}, {"goals", "extrapolated"}});
   }
 
   void material(Json& body, bool tears) {
@@ -169,8 +170,7 @@ class RandomScene {
     }
     m["density"] = dice_.uniform(900, 1100);
     m["damping"] = damping;
-    // A sixth of the bodies of elements have a viscosity, of up to a tenth of a second; some that shape matching leaves have b
-    // K.
+    // A sixth of the bodies of elements have a viscosity, of up to a tenth of a second; some have b K.
     Dice viscous(number_ ^ 0x632be59b), rayleigh(number_ ^ 0x2545f491);
     if (body["model"]["type"] == "tled" || body["model"]["type"] == "mass-spring")
       if (rayleigh.chance(0.1)) m["stiffness_damping"] = rayleigh.logarithmic(1e-5, 1e-2);

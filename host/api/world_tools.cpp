@@ -6,6 +6,7 @@
 #include "api/first_refusal.h"
 #include "api/world_call.h"
 #include "model/contact/tool_mesh.h"
+#include "model/matching/matching_step.h"
 #include "scene/tool_entry.h"
 #include "simulation/contact/tool_changes.h"
 #include "simulation/measure/tool_shapes.h"
@@ -45,7 +46,9 @@ void World::Impl::check_can_change_tools() {
 }
 
 std::string World::Impl::add_tool(ContactTool tool) {
-  check_takes_tools(scene);
+  Scene as_built = scene;
+  take_substeps(*model, as_built);
+  check_takes_tools(as_built);
   check_can_change_tools();
   const std::string name = rigid_tools.add(std::move(tool));
   settle_tools();

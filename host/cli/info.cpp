@@ -115,7 +115,7 @@ class Info {
                        springs ? std::string("tetrahedra of a network of springs")
                                : fmt::format("{} elements", pliant::to_string(b.element)),
                        b.spacing > 0 ? fmt::format(" on a lattice of {:.5g} m", b.spacing) : "", b.triangles));
-      if (b.matching_nodes + b.interface_nodes > 0) matching(b);
+      if (b.matching_nodes + b.interface_nodes > 0) matching(b, i);
       const double excess = b.surface_volume > 0 ? 100 * (b.volume / b.surface_volume - 1) : 0;
       line(fmt::format("  {:.4g} m large, between {}", fmt::join(size, " x "), corners_text(box)));
       line(fmt::format("  mass {:.6g} kg, volume {:.6g} m^3, inside its surface {:.6g} m^3 ({:+.2f} %)", b.mass, b.volume,
@@ -202,16 +202,21 @@ class Info {
   }
 
   /// One region of shape matching is centred at each node of its cells, the interface included.
-  void matching(const ModelBody& b) {
+  void matching(const ModelBody& b, std::size_t index) {
+    std::int32_t substeps = 1;
+    for (const FlsmBatch& batch : model_.flsm)
+      substeps = static_cast<std::size_t>(batch.body) == index ? batch.settings.substeps : substeps;
     const std::int64_t tled = b.operational_nodes + b.interface_nodes, regions = b.matching_nodes + b.interface_nodes;
     const double ratio = static_cast<double>(tled) / static_cast<double>(b.slot.size());
     json_["bodies"].back()["shape_matching"] = {{"operational_nodes", b.operational_nodes},
                                                 {"interface_nodes", b.interface_nodes},
                                                 {"matching_nodes", b.matching_nodes},
                                                 {"regions", regions},
+                                                {"substeps", substeps},
                                                 {"ratio", ratio}};
-    line(fmt::format("  shape matching: {} operational, {} interface and {} matching nodes (ratio {:.4g}), {} regions",
-                     b.operational_nodes, b.interface_nodes, b.matching_nodes, ratio, regions));
+    line(fmt::format("  shape matching: {} operational, {} interface and {} matching nodes (ratio {:.4g}), {} regions{}",
+                     b.operational_nodes, b.interface_nodes, b.matching_nodes, ratio, regions,
+                     substeps > 1 ? fmt::format(", once in {} steps", substeps) : ""));
   }
 
   void stable_step(double iterated_dt, double dt, const std::string& not_iterated) {

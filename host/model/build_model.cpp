@@ -16,6 +16,7 @@
 #include "model/links/build_links.h"
 #include "model/links/membranes.h"
 #include "model/matching/flsm.h"
+#include "model/matching/matching_step.h"
 #include "model/model.h"
 #include "model/nodes/boundary_conditions.h"
 #include "model/nodes/node_numbering.h"
@@ -354,6 +355,7 @@ Model build_model(const Scene& scene, std::span<const BodyMesh* const> solids) {
   add_surfaces(solids, model);
   add_membranes(scene, model);
   add_boundary_conditions(scene, model);
+  choose_substeps(scene, model);
   return model;
 }
 

@@ -47,6 +47,10 @@ Scene with_values(const Scene& scene, const Scene& values) {
     body.material = from.material;
     for (std::size_t i = 0; i < body.inclusions.size(); ++i) body.inclusions[i].material = from.inclusions.at(i).material;
     DeformationModel model = from.model;
+    if (model.substeps == 0) {  // "auto" is chosen at the start
+      model.substeps = body.model.substeps;
+      model.extrapolate = body.model.extrapolate;
+    }
     model.cells = body.model.cells;
     model.pointer = body.model.pointer;
     body.model = std::move(model);
@@ -202,6 +206,8 @@ Json after(const Scene& scene, const Json& before, const Reader& entry) {
     model.expect_object("model");
     if (!now.bodies[b].model.matches())
       model.fail("a model of a body without shape matching", "none: only the numbers of shape matching can change");
+    if (model.has("substeps") && model.at("substeps").json() == "auto")
+      model.at("substeps").fail("a whole number from 1 to 64: \"auto\" is chosen when a scene begins");
     kept["model"] = merged_model(body["model"], model);
   }
   if (entry.has("fixed")) {

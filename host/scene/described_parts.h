@@ -111,9 +111,10 @@ template <class V, class S>
 void describe_interface(V&& v, S&& s) {
   v(s.beta,
     {"beta", above(0).or_word("auto"), "N/m", "20", "stiffness of the interface; `\"auto\"`: alpha m / dt^2 of each node"});
-  v(s.substeps, {"substeps", from_to(1, 64), "", "4",
-                 "steps of TLED per step of FLSM; a run continues with 1 where more drive the elements apart "
-                 "([stability.md](stability.md))"});
+  v(s.substeps,
+    {"substeps", from_to(1, 64).or_word("auto"), "", "4",
+     "steps of TLED per step of FLSM; `\"auto\"`: as many as the stiffness of shape matching allows, 1 to 8, with "
+     "extrapolated goals; a run continues with 1 where more drive the elements apart ([stability.md](stability.md))"});
   v(goals_of(s), goals_words(),
     {"goals", any, "", "\"extrapolated\"",
      "`held`: the interface is pulled in the first substep (keeps momentum); `extrapolated`: in all of them (allows larger "

@@ -28,6 +28,19 @@ void refuse_senseless(const Reader& model, ModelType type) {
   refuse_both(model, "alpha", "stiffness", "at most one: a stiffness chooses alpha");
 }
 
+/// What automatic substeps cannot have beside them: it belongs to a step of shape matching, whose length is chosen.
+void check_automatic(const Reader& model, const DeformationModel& m) {
+  const auto refuse = [&](const char* key, const char* instead) {
+    model.at(key).fail(
+        fmt::format("no {} with \"substeps\": \"auto\": it belongs to a step of shape matching, whose length is chosen "
+                    "(give {} instead)",
+                    key, instead));
+  };
+  if (model.has("alpha")) refuse("alpha", "a \"stiffness\"");
+  if (m.damping > 0) refuse("damping", "a \"damping\" of the material");
+  if (model.has("goals") && !m.extrapolate) model.at("goals").fail("\"extrapolated\" with \"substeps\": \"auto\"");
+}
+
 Selection read_region(const Reader& region) {
   region.expect_object("region");
   if (region.has("box") == region.has("sphere")) {
@@ -56,6 +69,7 @@ DeformationModel read_model(const Reader& model, bool lattice) {
   describe_growth(ReadKeys{model}, m);
   describe_interface(ReadKeys{model}, m);
   describe_regions(ReadKeys{model}, m);
+  if (m.substeps == 0) check_automatic(model, m);
   describe_alpha(ReadKeys{model}, m);
   if (model.has("region")) m.region = read_region(model.at("region"));
   if (model.has("stiffness")) {

@@ -79,7 +79,7 @@ struct DeformationModel {
   double young = 0;                 ///< "stiffness": {"young": E} [Pa] determines alpha; 0: alpha is used directly
   bool matched = false;             ///< young is the material's by default; limited to the stiffness of an alpha of 1
   double damping = 0;               ///< per-region damping, in [0, 1] per step
-  int substeps = 1;                 ///< steps of TLED per step of FLSM, 1 to 64
+  int substeps = 1;                 ///< steps of TLED per step of FLSM, 1 to 64; 0: "auto"
   bool extrapolate = false;         ///< "goals": "extrapolated" instead of "held" between steps of FLSM
   bool conservative =
       true;         ///< "coupling": "conservative" returns the reaction of the interface to the regions, "one-sided" does not

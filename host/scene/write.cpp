@@ -149,6 +149,7 @@ OrderedJson model_json(const M& m) {
       describe_growth(WriteKeys{model}, m);
     }
     describe_interface(WriteKeys{model}, m);
+    if (m.substeps == 0) model.erase("goals");  // chosen with the substeps
   }
   describe_regions(WriteKeys{model}, m);
   add_matching(model, m);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "model/matching/matching_step.h"
 #include "model/nodes/ballast.h"
 #include "pliant/error.h"
 #include "program/hash.h"
@@ -39,6 +40,7 @@ void Simulation::load(std::shared_ptr<const Model> model) {
 
 void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptions& options) {
   settings_.batch_steps = options.batch_steps;
+  take_substeps(*model, scene_);
   parameters_.start();
   press_.start(*model);
   load(std::move(model));

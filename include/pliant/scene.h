@@ -71,7 +71,7 @@ struct ModelSpec {
   std::optional<double> young;  ///< modulus of the shape-matching part [Pa], instead of alpha; without both: a hybrid uses its
                                 ///< material's, flsm alpha = 0.5
   double damping = 0;           ///< per-region damping, in [0, 1]
-  int substeps = 1;             ///< hybrid: finite-element steps per step of shape matching
+  int substeps = 1;             ///< hybrid: finite-element steps per step of shape matching; 0: automatic
   SpringSpec spring;            ///< mass-spring: law of the springs
   bool edge_springs = true;     ///< mass-spring: springs along the edges of the tetrahedra
 };

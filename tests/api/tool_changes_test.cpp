@@ -288,6 +288,14 @@ TEST(ToolChanges, MisuseIsRefused) {
   relaxed.relaxation = RelaxationSpec{};
   World still(relaxed, on("cpu"));
   EXPECT_TRUE(has(message_of([&] { still.add_tool(ball("a", {0, 0, 0.05})); }), "relaxation"));
+  SceneSpec hybrid = bare_block();
+  hybrid.bodies[0].model.type = "hybrid";
+  hybrid.bodies[0].model.substeps = 0;  // automatic: several, as there is no tool
+  World several(hybrid, on("cpu"));
+  EXPECT_TRUE(has(message_of([&] { several.add_tool(ball("a", {0, 0, 0.05})); }), "substeps"));
+  hybrid.tools = {ball("first", {0, 0, 0.02})};
+  World single(hybrid, on("cpu"));
+  EXPECT_EQ(single.add_tool(ball("a", {0, 0, 0.05})), "a");
 }
 
 TEST(ToolChanges, ACutLeavesThem) {

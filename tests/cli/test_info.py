@@ -67,7 +67,8 @@ class Info(harness.CliTest):
         model = {"type": "hybrid", "width": 1, "region": {"box": [[-1, -1, -1], [1, -0.01, 1]]}}
         scene = self.scene(body={"model": model})
         self.assertEqual(self.json("info", scene)["bodies"][0]["shape_matching"],
-                         {"operational_nodes": 72, "interface_nodes": 36, "matching_nodes": 108, "regions": 144, "ratio": 0.5})
+                         {"operational_nodes": 72, "interface_nodes": 36, "matching_nodes": 108, "regions": 144,
+                          "substeps": 1, "ratio": 0.5})
         self.assertIn("72 operational, 36 interface and 108 matching nodes (ratio 0.5), 144 regions", self.pliant("info", scene).stdout)
         pure = self.json("info", self.scene(body={"model": {"type": "flsm"}}))["bodies"][0]["shape_matching"]
         self.assertEqual((pure["matching_nodes"], pure["regions"], pure["ratio"]), (216, 216, 0))

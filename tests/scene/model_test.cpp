@@ -1,4 +1,6 @@
 // The key "model": what arrives, what comes back, what is refused and with which words.
+#include <map>
+
 #include "scene/patched_scene.h"
 
 namespace pliant::model_test {
@@ -85,6 +87,21 @@ TEST(Model, EndsOfTheRangesAreAllowed) {
   }
 }
 
+TEST(Model, AutomaticSubstepsChooseTheirGoals) {
+  EXPECT_EQ(model_of(R"({"type": "hybrid", "substeps": "auto"})").substeps, 0);
+  EXPECT_EQ(message(with_model(R"({"type": "hybrid", "substeps": "auto", "goals": "extrapolated", "damping": 0})")), "");
+  const std::map<std::string, Json> refused{{"goals", "held"}, {"alpha", 0.5}, {"damping", 0.1}};
+  for (const auto& [key, value] : refused) {
+    Json model{{"type", "hybrid"}, {"substeps", "auto"}};
+    model[key] = value;
+    const std::string got = message(with_model(model.dump()));
+    EXPECT_EQ(got.find("dir/s.json: /bodies/0/model/" + key + ": got "), 0U) << got;
+    EXPECT_NE(got.find(R"("substeps": "auto")"), std::string::npos) << got;
+  }
+  EXPECT_NE(message(with_model(R"({"type": "hybrid", "substeps": 0})")).find("/bodies/0/model/substeps: got 0"),
+            std::string::npos);
+}
+
 TEST(Model, EveryElementMayBeOperational) {
   for (const char* element : {"hex8", "hex8full", "tet4", "tet4anp"}) {
     EXPECT_EQ(message(patched("{}", std::string(R"({"element": ")") + element + "\"}")), "") << element;
@@ -98,6 +115,7 @@ TEST(Model, RoundTripKeepsEverything) {
       R"({"type": "hybrid", "region": {"sphere": [[1, 2, 3], 0.7]}, "stiffness": {"young": 1234.5}, "beta": 3})",
       R"({"type": "hybrid", "region": {"box": [[0, 1, 2], [3, 4, 5]]}, "goals": "extrapolated"})",
       R"({"type": "hybrid"})",
+      R"({"type": "hybrid", "substeps": "auto", "stiffness": {"young": 900}})",
       R"({"type": "flsm", "width": 4, "alpha": 0.9, "damping": 0.2})",
       R"({"type": "flsm", "width": 5, "stiffness": {"young": 800}})"};
   for (const std::string& text : models) {
@@ -178,8 +196,8 @@ TEST(Model, ValuesOutOfRangeAreNamed) {
       {R"({"type": "flsm", "stiffness": {"young": 0}})", "/bodies/0/model/stiffness/young: got 0, expected a number > 0"},
       {R"({"type": "flsm", "damping": -0.1})", "/bodies/0/model/damping: got -0.1, expected a number with 0 <= damping <= 1"},
       {R"({"type": "flsm", "damping": 2})", "/bodies/0/model/damping: got 2, expected a number with 0 <= damping <= 1"},
-      {R"({"type": "hybrid", "substeps": 0})", "/bodies/0/model/substeps: got 0, expected a whole number from 1 to 64"},
-      {R"({"type": "hybrid", "substeps": 65})", "/bodies/0/model/substeps: got 65, expected a whole number from 1 to 64"},
+      {R"({"type": "hybrid", "substeps": 0})", "/bodies/0/model/substeps: got 0, expected \"auto\" or a whole"},
+      {R"({"type": "hybrid", "substeps": 65})", "/bodies/0/model/substeps: got 65, expected \"auto\" or a whole"},
       {R"({"type": "hybrid", "goals": "hold"})",
        R"(/bodies/0/model/goals: got "hold", expected one of held, extrapolated (did you mean "held"?))"},
       {R"({"type": "hybrid", "coupling": "onesided"})",

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/vec.h"
+#include "model/matching/matching_step.h"
 #include "simulation/step/coupling.h"
 
 namespace pliant {
@@ -20,12 +21,26 @@ constexpr double kMostWeight = 0.1;
 /// elements thick.
 constexpr double kTapered = 0.25, kSkew = 0.7;
 
+/// Of a given step: an automatic one is not longer.
+void add_extrapolation(const FlsmBatch& b, const Material& material, const std::string& name, double dt,
+                       std::vector<std::string>& remarks) {
+  const int n = b.settings.substeps;
+  if (n == 1 || !b.settings.extrapolate || b.interface == 0) return;
+  const double most = automatic_matching_step(b, material.damping, true) / n;
+  if (dt <= 1.00001 * most) return;
+  remarks.push_back(
+      fmt::format("body '{}': with {} substeps and extrapolated goals its interface may shake by itself at this step; a "
+                  "\"dt\" up to {:.4g} s, or \"auto\", is safe",
+                  name, n, most));
+}
+
 void add_matching(const Model& model, const Scene& scene, double dt, std::vector<std::string>& remarks) {
   for (const FlsmBatch& b : model.flsm) {
     const auto index = static_cast<std::size_t>(b.body);
     const Material& material = scene.bodies[index].material;
     const double modulus = matching_modulus(b, dt, material.damping), ratio = modulus / material.moduli.young();
     const std::string& name = model.bodies[index].name;
+    add_extrapolation(b, material, name, dt, remarks);
     if (b.interface > 0 && (ratio < 1 / kFarApart || ratio > kFarApart)) {
       remarks.push_back(
           fmt::format("body '{}': at this step its shape matching behaves like a modulus of {:.3g} Pa, {:.3g} times that "

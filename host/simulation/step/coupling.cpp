@@ -9,6 +9,7 @@
 #include <map>
 
 #include "geometry/vec.h"
+#include "model/matching/matching_step.h"
 #include "pliant/error.h"
 #include "simulation/step/stable_step.h"
 
@@ -18,29 +19,9 @@ namespace {
 /// Factor on beta while the interface force is active: see flsm_interface in program_flsm.cpp.
 int pull_factor(const DeformationModel& m) { return m.extrapolate ? 1 : m.substeps; }
 
-/// Young's modulus of shape matching is E = c rho d^2 alpha / b, with b = H^2 / (1 + D H / 2) for the step H and the damping
-/// rate D [1/s]. c, indexed by half-width minus one, is that of a uniaxial pull of bars of any thickness: (w^2 + w) / 3, the
-/// variance of a window of 2 w + 1 nodes. Measured by bench/calibrate.py; bending is stiffer if regions are thicker than the
-/// body (docs/flsm_stiffness.md).
-constexpr double kPullStiffness[] = {2.0 / 3, 2, 4, 20.0 / 3, 10};
-
-/// E b / alpha [Pa s^2], to which the modulus of a batch is proportional.
-double stiffness_unit(const FlsmBatch& batch) {
-  return kPullStiffness[batch.settings.width - 1] * batch.density * batch.spacing * batch.spacing;
-}
-
-/// b of a step h [s^2]: the displacement per acceleration in a step, with the damping rate D [1/s].
-double step_square(double h, double damping) { return h * h / (1 + 0.5 * damping * h); }
-
-/// The largest alpha for which shape matching is stable, with a margin: omega^2 H^2 = alpha times its highest mode, below 4.
-double largest_alpha(const FlsmBatch& batch) { return std::min(1.0, 3.8 / batch.stiffest); }
-
-/// The step of the scene at which alpha reaches that limit, the longest that "stiffness" allows [s].
+/// The step of the scene at which alpha reaches its limit, the longest that "stiffness" allows [s].
 double longest_step(const FlsmBatch& batch, double damping) {
-  const DeformationModel& m = batch.settings;
-  if (m.young <= 0) return std::numeric_limits<double>::infinity();
-  const double b = largest_alpha(batch) * stiffness_unit(batch) / m.young, quarter = 0.25 * damping * b;
-  return (quarter + std::sqrt(quarter * quarter + b)) / m.substeps;
+  return longest_matching_step(batch, damping) / batch.settings.substeps;
 }
 
 /// The alpha of a batch at the step `dt` of the scene [s] for the damping rate of its material [1/s]. A scene's alpha refers
@@ -162,7 +143,9 @@ bool has_finite_elements(const Model& model) {
 double longest_step(const Model& model, const Scene& scene) {
   double least = std::numeric_limits<double>::infinity();
   for (const FlsmBatch& b : model.flsm) {
-    least = std::min(least, longest_step(b, scene.bodies[static_cast<std::size_t>(b.body)].material.damping));
+    const double damping = scene.bodies[static_cast<std::size_t>(b.body)].material.damping;
+    const bool extrapolates = b.settings.extrapolate && b.settings.substeps > 1 && b.interface > 0;
+    least = std::min(least, automatic_matching_step(b, damping, extrapolates) / b.settings.substeps);
   }
   return least;
 }

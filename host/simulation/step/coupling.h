@@ -11,7 +11,7 @@ namespace pliant {
 /// Returns true if it has forces that limit the step: elements, springs, vessels or membranes.
 [[nodiscard]] bool has_elements(const Model& model);
 
-/// Returns the longest step that the "stiffness" of shape matching allows [s]; infinity without one.
+/// Returns the longest automatic step that the "stiffness" of shape matching allows [s]; infinity without one.
 [[nodiscard]] double longest_step(const Model& model, const Scene& scene);
 
 /// Returns the stable step including the interface springs [s], given that of the elements alone. This is a bound without an
