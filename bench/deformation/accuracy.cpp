@@ -7,6 +7,7 @@
 
 #include "backends/choice/backends.h"
 #include "bench/deformation/parts.h"
+#include "model/matching/matching_step.h"
 
 namespace pliant::bench {
 namespace {
@@ -95,13 +96,14 @@ double end_of_load(const Scene& scene) {
 struct Series {
   const char* name;
   bool matched = false;       ///< "stiffness" asks for the material's Young's modulus; otherwise alpha as in the scene
-  int substeps = 1;           ///< 3 stand at this step only with a small ratio: held goals resonate
+  int substeps = 1;           ///< 0: automatic; 3 stand at this step only with a small ratio: held goals resonate
   bool poisson_free = false;  ///< material of Poisson ratio 0 and the same modulus, as shape matching behaves
 };
 
 constexpr Series kSeries[]{{"alpha of the scene"},
                            {"stiffness matched", true},
                            {"stiffness matched, 2 substeps", true, 2},
+                           {"stiffness matched, automatic substeps", true, 0},
                            {"stiffness matched, nu = 0", true, 1, true}};
 
 class SeriesRun {
@@ -122,7 +124,7 @@ class SeriesRun {
     exact_ = simulate(run_, scene_, elements, dt_, end_, true);
     finish(exact_.row);
     if (series_.matched) body.model.young = young;
-    body.model.substeps = series_.substeps;
+    body.model.substeps = std::max(series_.substeps, 1);
     body.model.type = ModelType::flsm;
     matching_ = simulate(run_, scene_, model_of(scene_), dt_, end_, false);
     body.model.type = ModelType::hybrid;
@@ -141,7 +143,10 @@ class SeriesRun {
     run_.show(fmt::format("liver indented, hybrid of ratio {} ({})", ratio, series_.name));
     DeformationModel& settings = scene_.bodies[0].model;
     settings.ratio = ratio;
+    settings.substeps = series_.substeps;
+    settings.extrapolate = false;
     const auto model = model_of(scene_);
+    take_substeps(*model, scene_);
     const Outcome hybrid = simulate(run_, scene_, model, dt_, end_, true);
     const std::vector<int> layer = layers_of(*model);
     constexpr int kAll = std::numeric_limits<int>::max();

@@ -67,7 +67,7 @@ json describe(const Scene& scene) {
           {"blades", scene.blades.size()},
           {"tears", body.material.toughness > 0},
           {"width", body.model.width},
-          {"substeps", body.model.substeps},
+          {"substeps", body.model.substeps > 0 ? json(body.model.substeps) : json("auto")},
           {"load", load_of(body)},
           {"tools", scene.tools.size()},
           {"contact", scene.contact.has_value()},

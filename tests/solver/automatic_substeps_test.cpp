@@ -137,7 +137,7 @@ double noise(const Scene& scene) {
 /// Near the longest step of shape matching extrapolated goals feed energy to the interface: 0.3 to 0.5 m/s here, and more than
 /// its weight does.
 TEST(AutomaticSubsteps, TheInterfaceComesToRestWithExtrapolatedGoals) {
-  for (const int width : {1, 2}) {
+  for (const int width : {1, 2, 3}) {
     const double quiet = noise(block(width, 1));
     for (const int substeps : {0, 2, 4, 8}) {
       Scene scene = block(width, substeps);

@@ -17,9 +17,9 @@ constexpr std::int32_t kMostSubsteps = 8;  ///< beyond it shape matching takes h
 constexpr double kOverBound = 1.3;         ///< the stable step is usually 1 to 1.6 times the bound of the elements
 constexpr double kRegionCost = 3.5;        ///< time of a region of shape matching over that of an element (docs/speed.md)
 
-/// Of the longest step of shape matching with extrapolated goals: bodies of w = 1 shake from 0.6 on with 4 substeps, from 0.7
-/// on with 2 (docs/stability.md).
-constexpr double kExtrapolatedShare = 0.5;
+/// Of the longest step of shape matching with extrapolated goals. Bodies of w = 1 shake from 0.6 on with 4 substeps, those of w
+/// = 2 from 0.9 on (docs/stability.md).
+double extrapolated_share(const FlsmBatch& batch) { return batch.settings.width == 1 ? 0.5 : 0.7; }
 
 /// Hybrids that leave their substeps to the program, and may have several.
 struct Automatic {
@@ -77,7 +77,7 @@ double longest_matching_step(const FlsmBatch& batch, double damping) {
 }
 
 double automatic_matching_step(const FlsmBatch& batch, double damping, bool extrapolates) {
-  return (extrapolates ? kExtrapolatedShare : 1) * longest_matching_step(batch, damping);
+  return (extrapolates ? extrapolated_share(batch) : 1) * longest_matching_step(batch, damping);
 }
 
 void choose_substeps(const Scene& scene, Model& model) {
