@@ -47,10 +47,6 @@ Scene with_values(const Scene& scene, const Scene& values) {
     body.material = from.material;
     for (std::size_t i = 0; i < body.inclusions.size(); ++i) body.inclusions[i].material = from.inclusions.at(i).material;
     DeformationModel model = from.model;
-    if (model.substeps == 0) {  // "auto" is chosen at the start
-      model.substeps = body.model.substeps;
-      model.extrapolate = body.model.extrapolate;
-    }
     model.cells = body.model.cells;
     model.pointer = body.model.pointer;
     body.model = std::move(model);
