@@ -131,6 +131,9 @@ class Report {
                       name));
     }
     for (const std::string& sentence : parts_far_away(s_)) out_.remark(sentence);
+    std::int32_t substeps = 1;
+    for (const FlsmBatch& b : s_.model().flsm) substeps = std::max(substeps, b.settings.substeps);
+    json["substeps"] = substeps;
     json["most_substeps"] = s_.state().most_substeps;
     json["opened_edges"] = s_.state().opened;
     if (!s_.scene().joins.empty()) json["broken_joins"] = broken_joins();

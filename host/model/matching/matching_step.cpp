@@ -17,14 +17,18 @@ constexpr std::int32_t kMostSubsteps = 8;  ///< beyond it shape matching takes h
 constexpr double kOverBound = 1.3;         ///< the stable step is usually 1 to 1.6 times the bound of the elements
 constexpr double kRegionCost = 3.5;        ///< time of a region of shape matching over that of an element (docs/speed.md)
 
-/// Of the longest step of shape matching with extrapolated goals. Bodies of w = 1 shake from 0.6 on with 4 substeps, those of w
-/// = 2 from 0.9 on (docs/stability.md).
-double extrapolated_share(const FlsmBatch& batch) { return batch.settings.width == 1 ? 0.5 : 0.7; }
+/// Of the longest step of shape matching with extrapolated goals: beyond it the interface shakes (docs/stability.md).
+constexpr double kExtrapolatedShare = 0.5;
+
+/// Extrapolated goals feed a little energy to the interface at that step, too; damping that takes this fraction of the motion
+/// in a step of shape matching is more than enough.
+constexpr double kLeastDecay = 0.01;
 
 /// Hybrids that leave their substeps to the program, and may have several.
 struct Automatic {
   double single = std::numeric_limits<double>::infinity();   ///< step of shape matching with one substep [s]
   double several = std::numeric_limits<double>::infinity();  ///< with substeps [s]
+  double damping = std::numeric_limits<double>::infinity();  ///< least of their materials [1/s]
   double regions = 0;
 };
 
@@ -32,10 +36,11 @@ Automatic automatic_batches(const Scene& scene, const Model& model) {
   Automatic all;
   if (scene.contact || !scene.tools.empty() || !model.links.empty() || cuts_by_force(scene)) return all;
   for (const FlsmBatch& b : model.flsm) {
-    if (b.settings.substeps > 0 || b.interface == 0 || b.settings.young <= 0) continue;
+    if (b.settings.substeps > 0 || b.interface == 0 || b.settings.young <= 0 || b.settings.beta > 0) continue;
     const Material& material = scene.bodies[static_cast<std::size_t>(b.body)].material;
     all.single = std::min(all.single, automatic_matching_step(b, material.damping, false));
     all.several = std::min(all.several, automatic_matching_step(b, material.damping, true));
+    all.damping = std::min(all.damping, material.damping);
     all.regions += b.own + b.interface;
   }
   return all;
@@ -49,8 +54,9 @@ std::int32_t fastest(const Automatic& all, const Scene& scene, const Model& mode
   std::int32_t chosen = 1;
   for (std::int32_t n = 1; n <= kMostSubsteps; ++n) {
     if (n > 1 && scene.dt > 0 && n * scene.dt > all.several) break;
-    const double longest = n > 1 ? all.several / n : all.single;
-    const double cost = (elements + kRegionCost * all.regions / n) / std::min(step, longest);
+    const double dt = std::min(step, n > 1 ? all.several / n : all.single);
+    if (n > 1 && all.damping < least_damping(n * dt)) continue;
+    const double cost = (elements + kRegionCost * all.regions / n) / dt;
     if (cost < best) {
       best = cost;
       chosen = n;
@@ -77,15 +83,17 @@ double longest_matching_step(const FlsmBatch& batch, double damping) {
 }
 
 double automatic_matching_step(const FlsmBatch& batch, double damping, bool extrapolates) {
-  return (extrapolates ? extrapolated_share(batch) : 1) * longest_matching_step(batch, damping);
+  return (extrapolates ? kExtrapolatedShare : 1) * longest_matching_step(batch, damping);
 }
+
+double least_damping(double h) { return kLeastDecay / h; }
 
 void choose_substeps(const Scene& scene, Model& model) {
   const Automatic all = automatic_batches(scene, model);
   const std::int32_t n = all.regions > 0 ? fastest(all, scene, model) : 1;
   for (FlsmBatch& batch : model.flsm) {
     if (batch.settings.substeps > 0) continue;
-    const bool several = n > 1 && batch.interface > 0 && batch.settings.young > 0;
+    const bool several = n > 1 && batch.interface > 0 && batch.settings.young > 0 && batch.settings.beta == 0;
     batch.settings.substeps = several ? n : 1;
     batch.settings.extrapolate = several;
   }

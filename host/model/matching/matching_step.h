@@ -22,10 +22,14 @@ namespace pliant {
 /// extrapolated, which feed energy to an interface near it (docs/stability.md).
 [[nodiscard]] double automatic_matching_step(const FlsmBatch& batch, double damping, bool extrapolates);
 
+/// Returns the least damping of the material [1/s] that keeps extrapolated goals quiet at a step `h` of shape matching [s].
+[[nodiscard]] double least_damping(double h);
+
 /// Chooses the substeps of hybrids with `"substeps": "auto"`, the same for all, and extrapolated goals: those of 1 to 8 with
 /// which a second of the scene takes the least time by the numbers of elements and regions, the bound of the elements and
 /// the automatic step of shape matching. 1 where something acts on shape matching in every step: tools, contact, joins,
-/// membranes, vessels and blades that cut by force.
+/// membranes, vessels and blades that cut by force; where the
+/// material is damped less than least_damping(), and with a given beta.
 void choose_substeps(const Scene& scene, Model& model);
 /// Replaces `"auto"` in the scene by what was chosen for its model.
 void take_substeps(const Model& model, Scene& scene);

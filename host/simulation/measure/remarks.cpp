@@ -21,17 +21,18 @@ constexpr double kMostWeight = 0.1;
 /// elements thick.
 constexpr double kTapered = 0.25, kSkew = 0.7;
 
-/// Of a given step: an automatic one is not longer.
+/// Of substeps that the scene gives.
 void add_extrapolation(const FlsmBatch& b, const Material& material, const std::string& name, double dt,
                        std::vector<std::string>& remarks) {
   const int n = b.settings.substeps;
   if (n == 1 || !b.settings.extrapolate || b.interface == 0) return;
-  const double most = automatic_matching_step(b, material.damping, true) / n;
-  if (dt <= 1.00001 * most) return;
+  const double most = automatic_matching_step(b, material.damping, true) / n, damping = least_damping(n * std::min(dt, most));
+  if (dt <= 1.00001 * most && material.damping >= 0.99 * damping) return;
   remarks.push_back(
-      fmt::format("body '{}': with {} substeps and extrapolated goals its interface may shake by itself at this step; a "
-                  "\"dt\" up to {:.4g} s, or \"auto\", is safe",
-                  name, n, most));
+      fmt::format("body '{}': with {} substeps and extrapolated goals its interface may gain energy and shake; safe are a "
+                  "\"dt\" up to {:.4g} s "
+                  "with a \"damping\" of at least {:.3g} 1/s, or \"substeps\": \"auto\"",
+                  name, n, most, damping));
 }
 
 void add_matching(const Model& model, const Scene& scene, double dt, std::vector<std::string>& remarks) {

@@ -26,7 +26,7 @@ constexpr double kDamped = 0.03;  ///< fraction of tool forces from damping that
 void add_substeps(const Simulation& s, Sentences& out) {
   if (s.state().most_substeps == 0) return;
   out.push_back(
-      fmt::format("the pull of shape matching, several steps at once, drove finite elements apart; hybrids went on with "
+      fmt::format("finite elements burst or stiffened where shape matching pulls once in several steps; hybrids went on with "
                   "\"substeps\": {}",
                   s.state().most_substeps));
 }

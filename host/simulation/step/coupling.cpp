@@ -26,8 +26,8 @@ double longest_step(const FlsmBatch& batch, double damping) {
 
 /// The alpha of a batch at the step `dt` of the scene [s] for the damping rate of its material [1/s]. A scene's alpha refers
 /// to the first step, a "stiffness" to any step. Alpha decreases with the step: if the start is stable, every smaller step
-/// is. Throws Error if a "stiffness" needs more than the largest alpha.
-double alpha_for(const FlsmBatch& batch, double dt, double first_dt, double damping) {
+/// is. Throws Error if a "stiffness" needs more than the largest alpha; an `automatic` step follows a changed one.
+double alpha_for(const FlsmBatch& batch, double dt, double first_dt, double damping, bool automatic = false) {
   const DeformationModel& m = batch.settings;
   if (m.young <= 0) {
     // A constant alpha would stiffen a body whenever the step is shortened, which would shorten the step further.
@@ -36,7 +36,7 @@ double alpha_for(const FlsmBatch& batch, double dt, double first_dt, double damp
   }
   const double b = step_square(m.substeps * dt, damping);
   const double largest = largest_alpha(batch), most = largest * stiffness_unit(batch) / b;
-  if (m.young > 1.00001 * most && !m.matched) {  // tolerate the digits of the message
+  if (m.young > 1.00001 * most && !m.matched && !automatic) {  // tolerate the digits of the message
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}/stiffness/young: got {} Pa, which no alpha reaches with width {} at dt = {:.6g} s{}; allowed "
                             "is at most {:.6g} Pa, "
@@ -238,7 +238,7 @@ void upload_coupling(const RunContext& run) {
     const FlsmBatch& b = model.flsm[i];
     const double dt = run.state.clock.dt, h = b.settings.substeps * dt;
     const double damping = run.scene.bodies[static_cast<std::size_t>(b.body)].material.damping;
-    const double at_rest = alpha_for(b, dt, run.settings.first_dt, damping);
+    const double at_rest = alpha_for(b, dt, run.settings.first_dt, damping, run.settings.automatic);
     // The damping of dynamic relaxation reduces b; alpha is adapted so that the pull towards the goals, alpha m / b, does not
     // change.
     alpha.push_back(at_rest * (step_square(h, damping + run.state.relaxation.damping) / step_square(h, damping)));
