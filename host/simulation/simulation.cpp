@@ -62,6 +62,7 @@ void Simulation::start(std::shared_ptr<const Model> model, const SimulationOptio
     settings_.displacement_grid = std::ldexp(1.0, 22 + std::ilogb(settings_.increment_floor));
   }
   upload_coupling(run_);
+  if (!loaded_.model().displacement.empty()) start_goals(run_);
   set_initial_motion(run_);
 }
 

@@ -70,6 +70,20 @@ TEST(Follow, NothingJumpsWhenTheRegionMoves) {
   }
 }
 
+/// The first line of extrapolated goals after a move has no past: through the origin it would pull by half of the displacement.
+TEST(Follow, ExtrapolatedGoalsMoveTheBarAsOneSubstepDoes) {
+  const auto place = [](int substeps) {
+    Simulation sim(followed_bar(substeps), open_backend("cpu"));
+    while (sim.time() < 0.3) sim.advance(sim.next_batch(4));
+    EXPECT_FALSE(sim.state().regions.empty());
+    double most = 0;
+    for (const Vec3d& d : sim.displacements(0)) most = std::max(most, vec::norm(d));
+    return most;
+  };
+  const double alone = place(1);  // 0.061 m
+  for (const int substeps : {2, 4}) EXPECT_NEAR(place(substeps) / alone, 1, 0.04) << substeps;
+}
+
 /// The region begins in the left end; the tool stands where the right one ends, which is stretched to twice its length.
 Scene stretched_bar() {
   return parse_scene(R"({"format": "pliant-scene/1", "focus": {"path": [[0, 0.2, 0, 0]]},

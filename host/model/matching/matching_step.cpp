@@ -82,6 +82,10 @@ double longest_matching_step(const FlsmBatch& batch, double damping) {
   return quarter + std::sqrt(quarter * quarter + b);
 }
 
+bool extrapolates(const FlsmBatch& batch) {
+  return batch.settings.extrapolate && batch.settings.substeps > 1 && batch.interface > 0;
+}
+
 double automatic_matching_step(const FlsmBatch& batch, double damping, bool extrapolates) {
   return (extrapolates ? kExtrapolatedShare : 1) * longest_matching_step(batch, damping);
 }

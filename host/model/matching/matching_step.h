@@ -18,6 +18,9 @@ namespace pliant {
 /// without one.
 [[nodiscard]] double longest_matching_step(const FlsmBatch& batch, double damping);
 
+/// Returns true if goals at the interface of a batch are extrapolated between steps of shape matching.
+[[nodiscard]] bool extrapolates(const FlsmBatch& batch);
+
 /// Returns the step of shape matching that an automatic step allows [s]: less than the longest one where goals are
 /// extrapolated, which feed energy to an interface near it (docs/stability.md).
 [[nodiscard]] double automatic_matching_step(const FlsmBatch& batch, double damping, bool extrapolates);

@@ -6,6 +6,7 @@
 
 #include "geometry/vec.h"
 #include "model/links/membranes.h"
+#include "model/matching/matching_step.h"
 #include "model/nodes/ballast.h"
 #include "model/nodes/boundary_conditions.h"
 #include "schedule/build_program.h"
@@ -55,7 +56,8 @@ void ModelSwap::build(const Scene& scene, std::vector<NodeOrigins> origins, std:
   set_ballast(scene, *model_, ballast_);  // the last that can refuse a scene
   program_ = build_program(*model_, run_.program_options());
   same_nodes_ = keeps_state_ && keeps_nodes();
-  initial_ = initial_state(program_, same_nodes_ || program_.find("contact_start") >= 0);
+  const bool goals = std::any_of(model_->flsm.begin(), model_->flsm.end(), extrapolates);
+  initial_ = initial_state(program_, same_nodes_ || goals || program_.find("contact_start") >= 0);
   report_.model += clock_.lap();
 }
 
@@ -150,6 +152,7 @@ void ModelSwap::load_steps() {
   } else {
     carry_grips(run_, *model_, program_);
     carry_depths(run_, *model_, program_);
+    start_goals(*model_, program_.at(program_.find("node_u")).reals, program_);
   }
   run_.loaded.update(model_, std::move(program_));
   run_.state.look.tools = -1;

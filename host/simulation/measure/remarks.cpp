@@ -25,7 +25,7 @@ constexpr double kTapered = 0.25, kSkew = 0.7;
 void add_extrapolation(const FlsmBatch& b, const Material& material, const std::string& name, double dt,
                        std::vector<std::string>& remarks) {
   const int n = b.settings.substeps;
-  if (n == 1 || !b.settings.extrapolate || b.interface == 0) return;
+  if (!extrapolates(b)) return;
   const double most = automatic_matching_step(b, material.damping, true) / n, damping = least_damping(n * std::min(dt, most));
   if (dt <= 1.00001 * most && material.damping >= 0.99 * damping) return;
   remarks.push_back(

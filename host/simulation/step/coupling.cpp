@@ -144,8 +144,7 @@ double longest_step(const Model& model, const Scene& scene) {
   double least = std::numeric_limits<double>::infinity();
   for (const FlsmBatch& b : model.flsm) {
     const double damping = scene.bodies[static_cast<std::size_t>(b.body)].material.damping;
-    const bool extrapolates = b.settings.extrapolate && b.settings.substeps > 1 && b.interface > 0;
-    least = std::min(least, automatic_matching_step(b, damping, extrapolates) / b.settings.substeps);
+    least = std::min(least, automatic_matching_step(b, damping, extrapolates(b)) / b.settings.substeps);
   }
   return least;
 }
@@ -263,6 +262,27 @@ void upload_coupling(const RunContext& run) {
     run.backend().write_reals(mean, beta);
   }
   run.backend().write_reals(program.find("flsm_alpha"), alpha);
+}
+
+void start_goals(const Model& model, const std::vector<double>& u, Program& program) {
+  for (std::size_t i = 0; i < model.flsm.size(); ++i) {
+    const FlsmBatch& b = model.flsm[i];
+    if (!extrapolates(b)) continue;
+    Buffer& goals = program.at(program.find(fmt::format("flsm_goals/{}", i)));
+    goals.reals.resize(goals.values());
+    for (std::int32_t k = 0; k < b.interface; ++k)
+      std::copy_n(&u[4 * static_cast<std::size_t>(b.slot[b.own + k])], 3, &goals.reals[8 * static_cast<std::size_t>(k)]);
+  }
+}
+
+void start_goals(const RunContext& run) {
+  const Program& program = run.loaded.program();
+  Program started = program;
+  start_goals(run.model(), run.loaded.u(), started);
+  for (std::size_t i = 0; i < run.model().flsm.size(); ++i) {
+    const BufferId id = extrapolates(run.model().flsm[i]) ? program.find(fmt::format("flsm_goals/{}", i)) : -1;
+    if (id >= 0) run.backend().write_reals(id, started.at(id).reals);
+  }
 }
 
 }  // namespace pliant

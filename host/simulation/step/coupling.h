@@ -36,4 +36,10 @@ void check_beta(const RunContext& run, double dt, double elements_dt);
 /// Uploads alpha and beta for the current step. Throws Error (bad_input) for a "stiffness" that no alpha can reach.
 void upload_coupling(const RunContext& run);
 
+/// Gives extrapolated goals a past where none was computed: that the nodes were where they are now, `u` [slots][4] [m]. Without
+/// it the first line would go through the origin, and pull by a share of the displacement.
+void start_goals(const Model& model, const std::vector<double>& u, Program& program);
+/// The same for the loaded Program, whose nodes begin displaced.
+void start_goals(const RunContext& run);
+
 }  // namespace pliant
