@@ -108,7 +108,7 @@ class Cut(CliTest):
 
     def test_fewer_substeps_are_told(self):
         hybrid = {"material": {"young": 1000, "poisson": 0.4, "density": 1000},
-                  "model": {"type": "hybrid", "substeps": 8, "goals": "extrapolated"},
+                  "model": {"type": "hybrid", "substeps": 8, "goals": "held"},
                   "prescribed": [{"plane": [[0, 0.049, 0], [0, 1, 0]], "displacement": [0.03, -0.07, 0], "curve": "smooth", "duration": 0.2}]}
         pressed = self.scene(body=hybrid, gravity=[0, 0, 0])
         result = self.json("run", pressed, "--backend", "cpu", "--seconds", 0.3)
