@@ -151,6 +151,20 @@ TEST(AutomaticSubsteps, TheInterfaceComesToRestWithExtrapolatedGoals) {
   }
 }
 
+/// Blades keep the step at the bound of the elements, below what the choice expects.
+TEST(AutomaticSubsteps, AreNotToldToShakeThemselves) {
+  int several = 0;
+  for (double damping = 2; damping < 40; damping *= 1.03) {
+    Scene scene = block(2, 0, damping);
+    scene.gravity = {};
+    scene.blades.push_back(blade("knife", {{5, 0.02, 0.1, -1, 0.02, 0.1, 1}, {6, 0.02, -0.1, -1, 0.02, -0.1, 1}}));
+    const auto s = run_of(scene);
+    several += s->model().flsm.at(0).settings.substeps > 1;
+    EXPECT_TRUE(s->remarks().empty()) << damping;
+  }
+  EXPECT_GT(several, 0);
+}
+
 TEST(AutomaticSubsteps, AGivenStepThatLetsTheInterfaceShakeIsTold) {
   Scene scene = block(1, 3, 40);
   scene.bodies[0].model.extrapolate = true;

@@ -24,7 +24,12 @@ constexpr double kExtrapolatedShare = 0.5;
 /// in a step of shape matching is more than enough.
 constexpr double kLeastDecay = 0.01;
 
-/// Hybrids that leave their substeps to the program, and may have several.
+/// Whether a batch leaves its substeps to the program, and may have several.
+bool may_have_several(const FlsmBatch& b) {
+  return b.settings.substeps == 0 && b.interface > 0 && b.settings.young > 0 && b.settings.beta == 0;
+}
+
+/// Of all batches that may.
 struct Automatic {
   double single = std::numeric_limits<double>::infinity();   ///< step of shape matching with one substep [s]
   double several = std::numeric_limits<double>::infinity();  ///< with substeps [s]
@@ -36,7 +41,7 @@ Automatic automatic_batches(const Scene& scene, const Model& model) {
   Automatic all;
   if (scene.contact || !scene.tools.empty() || !model.links.empty() || cuts_by_force(scene)) return all;
   for (const FlsmBatch& b : model.flsm) {
-    if (b.settings.substeps > 0 || b.interface == 0 || b.settings.young <= 0 || b.settings.beta > 0) continue;
+    if (!may_have_several(b)) continue;
     const Material& material = scene.bodies[static_cast<std::size_t>(b.body)].material;
     all.single = std::min(all.single, automatic_matching_step(b, material.damping, false));
     all.several = std::min(all.several, automatic_matching_step(b, material.damping, true));
@@ -86,8 +91,8 @@ bool extrapolates(const FlsmBatch& batch) {
   return batch.settings.extrapolate && batch.settings.substeps > 1 && batch.interface > 0;
 }
 
-double automatic_matching_step(const FlsmBatch& batch, double damping, bool extrapolates) {
-  return (extrapolates ? kExtrapolatedShare : 1) * longest_matching_step(batch, damping);
+double automatic_matching_step(const FlsmBatch& batch, double damping, bool extrapolated) {
+  return (extrapolated ? kExtrapolatedShare : 1) * longest_matching_step(batch, damping);
 }
 
 double least_damping(double h) { return kLeastDecay / h; }
@@ -97,7 +102,7 @@ void choose_substeps(const Scene& scene, Model& model) {
   const std::int32_t n = all.regions > 0 ? fastest(all, scene, model) : 1;
   for (FlsmBatch& batch : model.flsm) {
     if (batch.settings.substeps > 0) continue;
-    const bool several = n > 1 && batch.interface > 0 && batch.settings.young > 0 && batch.settings.beta == 0;
+    const bool several = n > 1 && may_have_several(batch);
     batch.settings.substeps = several ? n : 1;
     batch.settings.extrapolate = several;
   }

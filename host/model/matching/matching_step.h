@@ -23,7 +23,7 @@ namespace pliant {
 
 /// Returns the step of shape matching that an automatic step allows [s]: less than the longest one where goals are
 /// extrapolated, which feed energy to an interface near it (docs/stability.md).
-[[nodiscard]] double automatic_matching_step(const FlsmBatch& batch, double damping, bool extrapolates);
+[[nodiscard]] double automatic_matching_step(const FlsmBatch& batch, double damping, bool extrapolated);
 
 /// Returns the least damping of the material [1/s] that keeps extrapolated goals quiet at a step `h` of shape matching [s].
 [[nodiscard]] double least_damping(double h);

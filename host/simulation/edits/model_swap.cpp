@@ -234,6 +234,7 @@ void ModelSwap::restore() {
   run_.loaded.write_w(old_w_);
   run_.place_surface();
   upload_coupling(run_);
+  start_goals(run_);
   if (!run_.state.forces.empty()) loads_.upload();
   run_.state.kept.reset();  // its copies are gone
 }

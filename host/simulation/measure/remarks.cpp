@@ -26,7 +26,7 @@ void add_extrapolation(const FlsmBatch& b, const Material& material, const std::
                        std::vector<std::string>& remarks) {
   const int n = b.settings.substeps;
   if (!extrapolates(b)) return;
-  const double most = automatic_matching_step(b, material.damping, true) / n, damping = least_damping(n * std::min(dt, most));
+  const double most = automatic_matching_step(b, material.damping, true) / n, damping = least_damping(n * most);
   if (dt <= 1.00001 * most && material.damping >= 0.99 * damping) return;
   remarks.push_back(
       fmt::format("body '{}': with {} substeps and extrapolated goals its interface may gain energy and shake; safe are a "

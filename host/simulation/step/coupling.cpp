@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "geometry/vec.h"
 #include "model/matching/matching_step.h"
@@ -264,25 +265,31 @@ void upload_coupling(const RunContext& run) {
   run.backend().write_reals(program.find("flsm_alpha"), alpha);
 }
 
-void start_goals(const Model& model, const std::vector<double>& u, Program& program) {
+namespace {
+
+/// Calls f(id of the buffer, values) for the extrapolated goals of each batch: [interface][2][4], the nodes where they are.
+template <class F>
+void for_each_start(const Model& model, const std::vector<double>& u, const Program& program, const F& f) {
   for (std::size_t i = 0; i < model.flsm.size(); ++i) {
     const FlsmBatch& b = model.flsm[i];
     if (!extrapolates(b)) continue;
-    Buffer& goals = program.at(program.find(fmt::format("flsm_goals/{}", i)));
-    goals.reals.resize(goals.values());
+    const BufferId id = program.find(fmt::format("flsm_goals/{}", i));
+    std::vector<double> goals(program.at(id).values());
     for (std::int32_t k = 0; k < b.interface; ++k)
-      std::copy_n(&u[4 * static_cast<std::size_t>(b.slot[b.own + k])], 3, &goals.reals[8 * static_cast<std::size_t>(k)]);
+      std::copy_n(&u[4 * static_cast<std::size_t>(b.slot[b.own + k])], 3, &goals[8 * static_cast<std::size_t>(k)]);
+    f(id, std::move(goals));
   }
 }
 
+}  // namespace
+
+void start_goals(const Model& model, const std::vector<double>& u, Program& program) {
+  for_each_start(model, u, program, [&](BufferId id, std::vector<double> goals) { program.at(id).reals = std::move(goals); });
+}
+
 void start_goals(const RunContext& run) {
-  const Program& program = run.loaded.program();
-  Program started = program;
-  start_goals(run.model(), run.loaded.u(), started);
-  for (std::size_t i = 0; i < run.model().flsm.size(); ++i) {
-    const BufferId id = extrapolates(run.model().flsm[i]) ? program.find(fmt::format("flsm_goals/{}", i)) : -1;
-    if (id >= 0) run.backend().write_reals(id, started.at(id).reals);
-  }
+  for_each_start(run.model(), run.loaded.u(), run.loaded.program(),
+                 [&](BufferId id, const std::vector<double>& goals) { run.backend().write_reals(id, goals); });
 }
 
 }  // namespace pliant

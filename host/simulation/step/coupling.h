@@ -39,7 +39,7 @@ void upload_coupling(const RunContext& run);
 /// Gives extrapolated goals a past where none was computed: that the nodes were where they are now, `u` [slots][4] [m]. Without
 /// it the first line would go through the origin, and pull by a share of the displacement.
 void start_goals(const Model& model, const std::vector<double>& u, Program& program);
-/// The same for the loaded Program, whose nodes begin displaced.
+/// The same for the loaded Program.
 void start_goals(const RunContext& run);
 
 }  // namespace pliant
