@@ -40,38 +40,46 @@ void ForceBlades::drive(const std::string& name, const BladeSegment& to, double 
                                               name, fmt::join(to[0], ", "), fmt::join(to[1], ", "), seconds));
   }
   const std::lock_guard lock(mutex_);
-  const auto own = [&](const Request& r) { return r.name == name; };
-  const auto last = std::find_if(asked_.rbegin(), asked_.rend(), own);
-  const auto before = last == asked_.rend() ? last : std::find_if(std::next(last), asked_.rend(), own);
+  Request* const last = asked_.newest([&](const Request& r) { return r.name == name; });
+  Request* const before = asked_.newest([&](const Request& r) { return r.name == name && &r < last; });
   // Of several pending drives the last one is kept, and the first, which may place the blade.
-  if (seconds > 0 && before != asked_.rend() && last->seconds > 0 && before->seconds >= 0) {
+  if (seconds > 0 && before != nullptr && last->seconds > 0 && before->seconds >= 0) {
     *last = {name, to, seconds};
   } else {
-    asked_.push_back({name, to, seconds});
+    asked_.push({name, to, seconds});
   }
 }
 
 void ForceBlades::lift(const std::string& name) {
   const std::lock_guard lock(mutex_);
-  asked_.push_back({name});
+  asked_.push({name});
 }
 
 void ForceBlades::hold_back() {
   const std::lock_guard lock(mutex_);
-  asked_.clear();
-  held_back_ = true;
+  asked_.hold_back();
 }
 
 void ForceBlades::go_on() {
   const std::lock_guard lock(mutex_);
-  held_back_ = false;
+  asked_.go_on();
+}
+
+void ForceBlades::add_save_point() {
+  const std::lock_guard lock(mutex_);
+  asked_.add_save_point();
+}
+
+void ForceBlades::remove_save_point() {
+  const std::lock_guard lock(mutex_);
+  asked_.remove_save_point();
 }
 
 void ForceBlades::renew(const Simulation& simulation, bool keep_requests) {
   {
     const std::lock_guard lock(mutex_);
     if (!keep_requests) asked_.clear();
-    held_back_ = false;
+    asked_.go_on();
   }
   note(simulation);
 }
@@ -85,8 +93,8 @@ void ForceBlades::apply(Simulation& simulation) {
   std::vector<Request> doing;
   {
     const std::lock_guard lock(mutex_);
-    if (asked_.empty() || held_back_) return;
-    doing = std::exchange(asked_, {});
+    doing = asked_.take();
+    if (doing.empty()) return;
   }
   FirstRefusal refusal;
   for (const Request& r : doing) {

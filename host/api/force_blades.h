@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "api/requests.h"
 #include "pliant/tool.h"
 #include "simulation/simulation.h"
 
@@ -19,9 +20,10 @@ class ForceBlades {
   [[nodiscard]] bool knows(const std::string& name) const;
   void drive(const std::string& name, const BladeSegment& to, double seconds);
   void lift(const std::string& name);
-  /// Discards all requests that are not executed yet, and executes none until renew() or go_on().
-  void hold_back();
+  void hold_back();  ///< as all of these: Requests
   void go_on();
+  void add_save_point();
+  void remove_save_point();
   [[nodiscard]] std::vector<BladeForce> forces() const;
 
   // For the stepping thread.
@@ -42,8 +44,7 @@ class ForceBlades {
 
   const std::vector<std::string> names_;
   mutable std::mutex mutex_;
-  std::vector<Request> asked_;
-  bool held_back_ = false;
+  Requests<Request> asked_;
   std::vector<BladeForce> forces_;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "api/first_refusal.h"
@@ -19,7 +20,7 @@ constexpr int kDoublings = 8;  ///< of the time that a tool may take through tis
 const ContactTool* RigidTools::find(const std::string& name) const {
   const auto own = tools_.find(name);
   const ContactTool* found = own == tools_.end() ? nullptr : &own->second;
-  for (const std::vector<Request>* list : {&doing_, &asked_}) {
+  for (const std::vector<Request>* list : {&std::as_const(doing_), &asked_.all()}) {
     for (const Request& r : *list) {
       if (r.name == name && (r.what == What::add || r.what == What::remove)) found = r.what == What::add ? &r.tool : nullptr;
     }
@@ -29,8 +30,14 @@ const ContactTool* RigidTools::find(const std::string& name) const {
 
 void RigidTools::check_known(const std::string& name) const {
   if (knows(name)) return;
+  std::set<std::string> known;
+  for (const auto& [other, tool] : tools_) known.insert(other);
+  for (const Request& r : doing_) known.insert(r.name);
+  for (const Request& r : asked_.all()) known.insert(r.name);
   std::string all;
-  for (const auto& [other, tool] : tools_) all += (all.empty() ? "\"" : ", \"") + other + "\"";
+  for (const std::string& other : known) {
+    if (knows(other)) all += (all.empty() ? "\"" : ", \"") + other + "\"";
+  }
   throw Error(ErrorCode::usage,
               fmt::format("there is no tool \"{}\"; {}", name, all.empty() ? "there are none" : "there are " + all));
 }
@@ -46,7 +53,7 @@ std::string RigidTools::add(ContactTool tool) {
                 fmt::format("there is a tool \"{}\" already, expected a different name for every tool", tool.name));
   }
   const std::string name = tool.name;
-  asked_.push_back({What::add, name, std::move(tool), std::move(form), {}, 0});
+  asked_.push({What::add, name, std::move(tool), std::move(form), {}, 0});
   return name;
 }
 
@@ -54,11 +61,11 @@ std::string RigidTools::add(ContactTool tool) {
 void RigidTools::ask(Request request) {
   const std::lock_guard lock(mutex_);
   check_known(request.name);
-  const auto last = std::find_if(asked_.rbegin(), asked_.rend(), [&](const Request& r) { return r.name == request.name; });
-  if (request.what == What::drive && last != asked_.rend() && last->what == What::drive) {
+  Request* const last = asked_.newest([&](const Request& r) { return r.name == request.name; });
+  if (request.what == What::drive && last != nullptr && last->what == What::drive) {
     *last = std::move(request);
   } else {
-    asked_.push_back(std::move(request));
+    asked_.push(std::move(request));
   }
 }
 
@@ -102,23 +109,32 @@ void RigidTools::set_mesh(const std::string& name, TriangleMesh mesh, double tim
       next_surface(name, std::move(mesh), time, before != nullptr ? *before : first_surface(tool)));
   const std::lock_guard lock(mutex_);
   given_[name] = next;
-  asked_.push_back({What::mesh, name, {}, nullptr, {}, 0, std::move(next)});
+  asked_.push({What::mesh, name, {}, nullptr, {}, 0, std::move(next)});
 }
 
 void RigidTools::drop_drives() {
   const std::lock_guard lock(mutex_);
-  std::erase_if(asked_, [](const Request& r) { return r.what == What::drive; });
+  asked_.discard_if([](const Request& r) { return r.what == What::drive; });
 }
 
 void RigidTools::hold_back() {
   const std::lock_guard lock(mutex_);
-  asked_.clear();
-  held_back_ = true;
+  asked_.hold_back();
 }
 
 void RigidTools::go_on() {
   const std::lock_guard lock(mutex_);
-  held_back_ = false;
+  asked_.go_on();
+}
+
+void RigidTools::add_save_point() {
+  const std::lock_guard lock(mutex_);
+  asked_.add_save_point();
+}
+
+void RigidTools::remove_save_point() {
+  const std::lock_guard lock(mutex_);
+  asked_.remove_save_point();
 }
 
 std::vector<ToolForce> RigidTools::forces() {
@@ -207,27 +223,27 @@ void RigidTools::make(Simulation& simulation, const Request& request) {
 
 /// A tool that would be driven through tissue too fast for contact goes there in more time.
 void RigidTools::drive_in_time(Simulation& simulation, const Request& request, std::vector<Slowed>& slowed) {
-  std::exception_ptr first;
-  double seconds = request.seconds;
-  for (int i = 0; i < kDoublings; ++i, seconds *= 2) {
-    try {
-      simulation.tools().drive(request.name, request.to, seconds);
-      if (first != nullptr) slowed.push_back({request.name, request.seconds, seconds});
-      return;
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::bad_input) throw;
-      if (first == nullptr) first = std::current_exception();
-    }
+  ToolEdits& tools = simulation.tools();
+  try {
+    tools.drive(request.name, request.to, request.seconds);
+    slow_.erase(request.name);
+    return;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_input || !tools.is_fast(request.name, request.to, request.seconds)) throw;
+    double seconds = request.seconds;
+    for (int i = 1; i < kDoublings && tools.is_fast(request.name, request.to, seconds); ++i) seconds *= 2;
+    if (tools.is_fast(request.name, request.to, seconds)) throw;
+    tools.drive(request.name, request.to, seconds);
+    if (slow_.insert(request.name).second) slowed.push_back({request.name, request.seconds, seconds});
   }
-  std::rethrow_exception(first);
 }
 
 void RigidTools::apply(Simulation& simulation, std::vector<Slowed>* slowed) {
   refused_.clear();
   {
     const std::lock_guard lock(mutex_);
-    if (asked_.empty() || held_back_) return;
-    doing_ = std::exchange(asked_, {});
+    doing_ = asked_.take();
+    if (doing_.empty()) return;
   }
   FirstRefusal refusal;
   for (const Request& request : doing_) {
@@ -284,7 +300,7 @@ void RigidTools::renew(const Simulation& simulation, bool keep_requests) {
   {
     const std::lock_guard lock(mutex_);
     if (!keep_requests) asked_.clear();
-    held_back_ = false;
+    asked_.go_on();
     made_again_ = simulation.report().made_again;
     given_.clear();
     traces_.clear();

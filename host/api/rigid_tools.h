@@ -3,10 +3,12 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "api/force_trace.h"
+#include "api/requests.h"
 #include "pliant/tool.h"
 #include "simulation/simulation.h"
 
@@ -31,16 +33,17 @@ class RigidTools {
   void set_mesh(const std::string& name, TriangleMesh mesh, double time);
   /// Discards drives that are not executed yet.
   void drop_drives();
-  /// Discards all requests that are not executed yet, and executes none until renew() or go_on().
-  void hold_back();
+  void hold_back();  ///< as all of these: Requests
   void go_on();
+  void add_save_point();
+  void remove_save_point();
   [[nodiscard]] std::vector<ToolForce> forces();
   /// The force in each of the last steps after step `after`. Throws Error (usage) for an unknown tool.
   [[nodiscard]] std::vector<ForceSample> trace(const std::string& name, std::int64_t after);
 
   // For the stepping thread.
 
-  /// A drive that takes more time than was asked for.
+  /// The first of some drives in succession that take more time than was asked for.
   struct Slowed {
     std::string name;
     double asked = 0, seconds = 0;
@@ -78,7 +81,7 @@ class RigidTools {
 
   void ask(Request request);
   static void make(Simulation& simulation, const Request& request);
-  static void drive_in_time(Simulation& simulation, const Request& request, std::vector<Slowed>& slowed);
+  void drive_in_time(Simulation& simulation, const Request& request, std::vector<Slowed>& slowed);
   void settle(const Simulation& simulation);
   void renew_given(const Simulation& simulation, const std::string& name);
 
@@ -86,8 +89,8 @@ class RigidTools {
   std::map<std::string, ContactTool> tools_;                           ///< those of the simulation after the last apply()
   std::map<std::string, std::shared_ptr<const GivenSurfaces>> given_;  ///< the last surfaces of tools that set_mesh() changes
   std::vector<Request> doing_;                                         ///< being executed
-  std::vector<Request> asked_;                                         ///< queued after these
-  bool held_back_ = false;
+  Requests<Request> asked_;                                            ///< queued after these
+  std::set<std::string> slow_;  ///< tools whose last drive took more time; used by the stepping thread
   std::string refused_;
   std::int64_t made_again_ = 0;  ///< RunReport::made_again at the last record()
   std::vector<ToolForce> forces_;

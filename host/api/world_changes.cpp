@@ -16,8 +16,7 @@ void World::Impl::change_pending() {
   std::vector<std::string> changes;
   {
     const std::lock_guard lock(mutex);
-    if (replacing) return;  // they are for the simulation to come
-    changes.swap(pending_changes);
+    changes = pending_changes.take();
   }
   if (changes.empty()) return;
   std::exception_ptr refused;  // the others are made nevertheless
@@ -43,7 +42,7 @@ void World::Impl::change(const std::string& text) {
   bool now = false;
   {
     const std::lock_guard lock(mutex);
-    pending_changes.push_back(text);
+    pending_changes.push(text);
     now = !job && !beside && !report.diverged && lost.empty();
   }
   if (!now) return;

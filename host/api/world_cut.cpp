@@ -99,8 +99,8 @@ void World::Impl::cut_pending() {
   std::vector<api::CutRequest> requests;
   {
     const std::lock_guard lock(mutex);
-    if (replacing || simulation->edits().building()) return;  // they are for the simulation to come, or after that edit
-    requests.swap(pending_cuts);
+    if (simulation->edits().building()) return;  // they come after that edit
+    requests = pending_cuts.take();
   }
   std::exception_ptr refused;  // the others are made nevertheless
   const auto moves = [&](std::size_t r) { return !requests[r].pose.empty(); };
@@ -108,7 +108,7 @@ void World::Impl::cut_pending() {
     if (simulation->edits().building()) {  // those that are left come after that edit, too
       const std::lock_guard lock(mutex);
       const auto left = requests.begin() + static_cast<std::ptrdiff_t>(first);
-      if (!replacing) pending_cuts.insert(pending_cuts.begin(), left, requests.end());
+      pending_cuts.put_back(left, requests.end());
       break;
     }
     last = first + 1;
@@ -127,14 +127,14 @@ CutResult World::Impl::cut(api::CutRequest request) {
   {
     const std::lock_guard lock(mutex);
     result.pending = job != nullptr || pace.running();
-    if (result.pending) pending_cuts.push_back(std::move(request));
+    if (result.pending) pending_cuts.push(std::move(request));
   }
   if (result.pending) return result;
   throw_failure();
   check_can_step();
   if (beside) {
     const std::lock_guard lock(mutex);
-    pending_cuts.push_back(std::move(request));
+    pending_cuts.push(std::move(request));
     result.pending = true;
     return result;
   }
@@ -206,7 +206,7 @@ void World::lift_blade(const std::string& blade) {
   const std::string name = key->second;
   impl_->blade_key.erase(key);
   const std::lock_guard lock(impl_->mutex);
-  impl_->pending_cuts.push_back({{}, {}, name});
+  impl_->pending_cuts.push({{}, {}, name});
 }
 
 void World::drive_blade(const std::string& blade, const Vec3d& a, const Vec3d& b, double seconds) {

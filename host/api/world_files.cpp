@@ -18,6 +18,21 @@ namespace {
 /// Returns true if a request replaces the simulation.
 bool replaces(const FileRequest& r) { return r.what == FileRequest::What::load || r.what == FileRequest::What::reset; }
 
+/// What an event says about a request that was served.
+std::string text_of(const FileRequest& r, double time) {
+  switch (r.what) {
+    case FileRequest::What::save:
+      return fmt::format("the state at {:.4g} s is in {}", time, r.file);
+    case FileRequest::What::load:
+      return fmt::format("the World goes on at {:.4g} s from {}", time, r.file);
+    case FileRequest::What::reset:
+      return "the World is back at its start";
+    case FileRequest::What::recover:
+      return fmt::format("the World goes on at {:.4g} s from the last good state, at rest", time);
+  }
+  return {};
+}
+
 void check_there(const std::string& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored))
@@ -34,6 +49,30 @@ void stop_motion(std::vector<std::uint8_t>& w, const std::vector<std::uint8_t>& 
       std::memcpy(w.data() + at, u.data() + at, 3 * sizeof(Real));  // the displacement of the step before
     }
   }
+}
+
+}  // namespace
+
+namespace {
+
+/// Saves what the World has with all that was asked of it before, and nothing that was asked since.
+void save_in_turn(World::Impl& world, const std::string& file) {
+  const auto end = [&world] {
+    const std::lock_guard lock(world.mutex);
+    world.pending_cuts.remove_save_point();
+    world.pending_changes.remove_save_point();
+    world.rigid_tools.remove_save_point();
+    world.force_blades.remove_save_point();
+  };
+  try {
+    api::check_device(world);
+    if (!world.report.diverged) world.make_changes(true);
+    world.save(file);
+  } catch (...) {
+    end();
+    throw;
+  }
+  end();
 }
 
 }  // namespace
@@ -82,12 +121,18 @@ bool World::Impl::leave_to_worker(FileRequest request) {
     if (!pace.running()) return false;
     if (replaces(request)) {
       replacing = true;  // what the caller asked for before this is void, and what it asks for from now on is for the next
-      pending_cuts.clear();
-      pending_changes.clear();
+      pending_cuts.hold_back();
+      pending_changes.hold_back();
       rigid_tools.hold_back();
       handles->hold_back();
       force_blades.hold_back();
       blade_key.clear();
+    }
+    if (request.what == FileRequest::What::save) {
+      pending_cuts.add_save_point();
+      pending_changes.add_save_point();
+      rigid_tools.add_save_point();
+      force_blades.add_save_point();
     }
     files.push_back(std::move(request));
   }
@@ -111,9 +156,7 @@ bool World::Impl::serve_file(const FileRequest& request) {
   }
   switch (request.what) {
     case FileRequest::What::save:
-      api::check_device(*this);
-      if (!report.diverged) make_changes(true);  // what was asked for before it
-      save(request.file);
+      save_in_turn(*this, request.file);
       return true;
     case FileRequest::What::recover:
       api::check_device(*this);
@@ -139,6 +182,7 @@ void World::Impl::serve_files() {
     Event event = api::event_of(words[static_cast<int>(r.what)], r.file, 0, {});
     try {
       if (!serve_file(r)) break;
+      event.text = text_of(r, simulation->time());
     } catch (const std::exception& error) {
       event.kind = "refused";
       event.text = error.what();
@@ -154,6 +198,8 @@ void World::Impl::serve_files() {
     halted = report.diverged || !lost.empty();
     replacing = std::any_of(files.begin(), files.end(), replaces);
     if (!replacing) {
+      pending_cuts.go_on();
+      pending_changes.go_on();
       rigid_tools.go_on();
       handles->go_on();
       force_blades.go_on();

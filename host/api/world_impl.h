@@ -17,6 +17,7 @@
 #include "api/force_blades.h"
 #include "api/frame_queue.h"
 #include "api/pace.h"
+#include "api/requests.h"
 #include "api/rigid_tools.h"
 #include "api/surface_handles.h"
 #include "api/trust.h"
@@ -31,7 +32,6 @@ namespace pliant {
 using OpenBackend = std::function<std::unique_ptr<Backend>(std::string* reason, std::int64_t nodes)>;
 
 namespace api {
-
 /// A rejected cut or tool change; the simulation is unchanged.
 struct Refused : Error {
   using Error::Error;
@@ -166,12 +166,12 @@ struct World::Impl {
   std::condition_variable changed;
   std::thread worker;
   bool stop = false;
-  std::function<void()> job;                  ///< work for the worker; empty: idle
-  std::vector<api::CutRequest> pending_cuts;  ///< made before the worker's next batch
-  std::vector<std::string> pending_changes;   ///< likewise, after them
-  std::string asked_parameters;               ///< used by the caller: parameters after all changes (scene/change.h)
-  bool beside = false;                        ///< used by the caller: asynchronous steps were started and not waited for
-  bool cut_since_read = false;                ///< the newest frame does not include the last cut
+  std::function<void()> job;                    ///< work for the worker; empty: idle
+  api::Requests<api::CutRequest> pending_cuts;  ///< made before the worker's next batch
+  api::Requests<std::string> pending_changes;   ///< likewise, after them
+  std::string asked_parameters;                 ///< used by the caller: parameters after all changes (scene/change.h)
+  bool beside = false;                          ///< used by the caller: asynchronous steps were started and not waited for
+  bool cut_since_read = false;                  ///< the newest frame does not include the last cut
   std::vector<std::shared_ptr<haptics::Instrument>> instruments;
   api::Pace pace;
   bool held = false;                              ///< a call that waits is at work; no frame may begin

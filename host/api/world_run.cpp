@@ -290,8 +290,8 @@ void World::Impl::restart(std::shared_ptr<Simulation> fresh, bool keep_requests)
     const std::lock_guard lock(mutex);
     failure = nullptr;
     loaded_parameters.reset();
-    pending_cuts.clear();
-    pending_changes.clear();
+    pending_cuts = {};
+    pending_changes = {};
   }
   publish_clock();
   read_frame(true);

@@ -104,5 +104,34 @@ TEST(Trust, ATooFastDriveThroughTissueTakesMoreTime) {
   EXPECT_NEAR(world.tool_forces().front().position[1], 0.06, 1e-9);
 }
 
+/// A hand asks for the same place at every picture: that its tool is late is news only once.
+TEST(Trust, TooFastDrivesInSuccessionAreToldOnce) {
+  SceneSpec scene = block(0);
+  scene.gravity = {};
+  ToolSpec ball;
+  ball.name = "ball";
+  ball.path = {{0, 0.05, 0.2, 0.03, 0, 0, 0, 1}};
+  scene.tools = {ball};
+  World world(scene, on("cpu"));
+  world.run_live({100, 0.2});
+  int told = 0, drives = 0;
+  const auto listen = [&] {
+    for (const Event& e : world.events()) told += e.kind == "slowed" ? 1 : 0;
+  };
+  for (int round = 1; round <= 2; ++round) {
+    for (int i = 0; i < 2000 && told < round; ++i, ++drives, listen()) {
+      world.drive_tool("ball", {0.05, 0.05, 0.03}, {0, 0, 0, 1}, 1e-3);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    for (int i = 0; i < 10; ++i, listen()) {
+      world.drive_tool("ball", {0.05, 0.05, 0.03}, {0, 0, 0, 1}, 1e-3);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_EQ(told, round);
+    world.drive_tool("ball", {0.05, 0.2, 0.03}, {0, 0, 0, 1}, 1);  // slow enough
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
+
 }  // namespace
 }  // namespace pliant::trust_test

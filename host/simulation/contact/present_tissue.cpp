@@ -71,7 +71,8 @@ const SurfaceDistance* PresentTissue::surface() const {
   return surface_.get();
 }
 
-ToolOverlap PresentTissue::overlap(const ToolForm& form, const Pose& pose, double time, std::size_t samples) const {
+/// The deepest contact point in a tool.
+ToolOverlap PresentTissue::overlap_of_points(const ToolForm& form, const Pose& pose, double time) const {
   const ToolMoment moment = tool_moment(form, time);
   const Pose at = compose(pose, moment.pose);
   ToolOverlap most;
@@ -80,6 +81,14 @@ ToolOverlap PresentTissue::overlap(const ToolForm& form, const Pose& pose, doubl
     const double depth = -tool_distance(form, place_back(at, points_[i]), moment);
     if (depth > most.depth) most = {depth, model_.contact->body[i], points_[i]};
   }
+  return most;
+}
+
+ToolOverlap PresentTissue::overlap(const ToolForm& form, const Pose& pose, double time, std::size_t samples) const {
+  if (form.shape != ToolShape::half_space && box_.distance2(pose.position) > form.reach * form.reach) return {};
+  ToolOverlap most = overlap_of_points(form, pose, time);
+  const ToolMoment moment = tool_moment(form, time);
+  const Pose at = compose(pose, moment.pose);
   for (const Vec3d& y : tool_samples(form, moment, samples)) {
     const Vec3d x = place(at, y);
     if (box_.distance2(x) > 0 || surface() == nullptr || !surface()->inside(x)) continue;
@@ -105,12 +114,17 @@ ToolOverlap PresentTissue::in_the_way(const ToolForm& form, const Pose& from, co
   const double allowed = std::max(tool_start_depth * cell, overlap(form, from, time, kSamplesOnTheWay).depth);
   const double looks = std::ceil((last - first) * travel(form, from, to) / (kStride * cell));
   const auto count = static_cast<std::size_t>(std::clamp(looks, 1.0, static_cast<double>(kMostLooks)));
-  for (std::size_t i = 0; i <= count; ++i) {
-    const double s = first + (last - first) * static_cast<double>(i) / static_cast<double>(count);
-    const ToolOverlap found = overlap(form, between(from, to, s), time, kSamplesOnTheWay);
-    if (found.depth > allowed) return found;
-  }
-  return {};
+  const auto look = [&](const auto& overlap_at) {
+    for (std::size_t i = 0; i <= count; ++i) {
+      const double s = first + (last - first) * static_cast<double>(i) / static_cast<double>(count);
+      const ToolOverlap found = overlap_at(between(from, to, s));
+      if (found.depth > allowed) return found;
+    }
+    return ToolOverlap{};
+  };
+  // Points of the tissue first: points of the tool need the surface, which takes far longer to make than to look at.
+  const ToolOverlap found = look([&](const Pose& at) { return overlap_of_points(form, at, time); });
+  return found.depth > 0 ? found : look([&](const Pose& at) { return overlap(form, at, time, kSamplesOnTheWay); });
 }
 
 void PresentTissue::refuse_inside(const std::string& name, const ToolForm& form, const Pose& pose, double time) const {

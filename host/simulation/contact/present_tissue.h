@@ -48,6 +48,7 @@ class PresentTissue {
                          double seconds) const;
 
  private:
+  [[nodiscard]] ToolOverlap overlap_of_points(const ToolForm& form, const Pose& pose, double time) const;
   [[nodiscard]] Vec3d placed(const Vec3d& rest, const std::int32_t* nodes, const double* weights) const;
   [[nodiscard]] const SurfaceDistance* surface() const;
 

@@ -182,6 +182,14 @@ Pose ToolEdits::within_reach(const std::string& name, const Pose& to, double sec
   return between(from, to, kReserve * share);
 }
 
+bool ToolEdits::is_fast(const std::string& name, const Pose& to, double seconds) const {
+  const Model& model = run_.model();
+  if (!touchable(model)) return false;
+  const ContactTool& tool = known(name);
+  const Pose from = tool_pose(tool, run_.state, run_.state.clock.time());
+  return is_too_fast(present_form(tool, run_.state.tools.given), from, to, seconds, model.contact->spacing);
+}
+
 void ToolEdits::drive(const std::string& name, const Pose& to, double seconds) {
   const ContactTool& tool = known(name);
   check_drive(name, to, seconds);

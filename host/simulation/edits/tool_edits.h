@@ -35,6 +35,8 @@ class ToolEdits {
   /// Moves a tool from its current pose to another within `seconds` [s]. Unparks it. Throws Error (bad_input) if it is too
   /// fast and tissue is in its way.
   void drive(const std::string& name, const Pose& to, double seconds);
+  /// Returns true if drive() looks whether the way is free: the tool is too fast for contact.
+  [[nodiscard]] bool is_fast(const std::string& name, const Pose& to, double seconds) const;
   /// Of a tool of the model: `to`, or if drive() would refuse that, how far it may go on the straight way there.
   [[nodiscard]] Pose within_reach(const std::string& name, const Pose& to, double seconds) const;
 
