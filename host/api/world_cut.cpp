@@ -25,11 +25,9 @@ std::string text_of(const CutReport& done, BladeMethod method) {
   if (method == BladeMethod::removal) what = "elements were removed";
   std::string text = fmt::format("{} {} in {:.3g} s", done.edges, what, done.seconds());
   if (method == BladeMethod::removal) text += fmt::format("; {:.4g} kg went with them", done.mass_lost);
-  if (method == BladeMethod::decomposition) {
-    text += fmt::format("; {} more elements", done.elements);
-    if (done.step_after < done.step_before)
-      text += fmt::format("; the step fell from {:.4g} s to {:.4g} s", done.step_before, done.step_after);
-  }
+  if (method == BladeMethod::decomposition) text += fmt::format("; {} more elements", done.elements);
+  if (done.step_after < done.step_before)
+    text += fmt::format("; the step fell from {:.4g} s to {:.4g} s", done.step_before, done.step_after);
   if (done.in_part > 0) text += fmt::format("; {} elements were cut in part and hold together", done.in_part);
   return text;
 }

@@ -90,6 +90,7 @@ TEST(Live, CutsAndToolsAreTakenUpAndToldAsEvents) {
   EXPECT_TRUE(world.cut({{{{-1, 0.045, -1}, {-1, 0.045, 3}, {3, 0.045, -1}}}}).pending);
   const Event cut = told.wait_for("cut");
   EXPECT_GT(cut.amount, 10);
+  EXPECT_NE(cut.text.find("the step fell from"), std::string::npos) << cut.text;  // there was no blade before
   ASSERT_TRUE(cut.placed);
   EXPECT_NEAR(cut.position[1], 0.045, 0.02);
   const Event pieces = told.wait_for("pieces");

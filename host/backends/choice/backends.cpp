@@ -58,9 +58,11 @@ Candidate first_bit_exact(const std::vector<BackendInfo>& devices, const std::st
   return candidate;
 }
 
-/// Below this one thread is faster than two with PoCL 3.1: 0.15 against 0.23 ms per step for a hybrid of 2900 nodes, 0.61
-/// against 0.46 for shape matching of 10,000.
-constexpr std::int64_t kFewNodes = 6000;
+/// Below this one thread of PoCL 3.1 is about as fast as two, and loses less where others compute: two busy processes beside
+/// a trainer of 10,000 nodes leave it 0.25 of real time on one thread, 0.09 to 0.23 on two.
+constexpr std::int64_t kFewNodes = 12000;
+/// Below this one run of a scene computes on the twins.
+constexpr std::int64_t kNoKernels = 6000;
 
 /// The twins: PoCL takes 0.4 s to start with its kernels compiled and 3 to 40 s without, more than its faster steps win back in
 /// one run of a small scene. nullptr where this processor cannot run them.
@@ -90,7 +92,7 @@ std::unique_ptr<Backend> open_auto(std::string& why, std::int64_t nodes, Backend
     return std::move(gpu.backend);
   }
   const bool few = nodes > 0 && nodes < kFewNodes;
-  if (few && use == BackendUse::once) {
+  if (few && nodes < kNoKernels && use == BackendUse::once) {
     if (auto cpu = open_without_compiling()) {
       why = fmt::format("cpu ({}): nothing to compile for one run of a small scene, and there is no bit-exact GPU{}",
                         cpu->info().device, gpu.skipped);
