@@ -25,9 +25,10 @@ class Requests {
     for (std::size_t& p : points_) p -= count;
     return taken;
   }
-  /// Puts some that were taken back to where they were.
+  /// Puts some that were taken back to where they were, unless they have become void since.
   template <class Iterator>
   void put_back(Iterator first, Iterator last) {
+    if (held_ && before_ == 0) return;
     all_.insert(all_.begin(), first, last);
     for (std::size_t& p : points_) p += static_cast<std::size_t>(last - first);
   }

@@ -303,6 +303,7 @@ void RigidTools::renew(const Simulation& simulation, bool keep_requests) {
     asked_.go_on();
     made_again_ = simulation.report().made_again;
     given_.clear();
+    slow_.clear();
     traces_.clear();
     blades_.clear();
     for (const std::string& name : simulation.press().names()) blades_[name] = {};

@@ -69,6 +69,12 @@ TEST(Requests, OfASimulationThatIsReplacedAreVoidUnlessASaveComesFirst) {
   EXPECT_EQ(taken(r), Ints{});
   r.go_on();
   EXPECT_EQ(taken(r), Ints{5});
+  r.remove_save_point();
+  r.hold_back();
+  const Ints void_now{6};
+  r.put_back(void_now.begin(), void_now.end());  // they were taken for the simulation that ends
+  r.go_on();
+  EXPECT_EQ(taken(r), Ints{});
 }
 
 ToolSpec ball() {
