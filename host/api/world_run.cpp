@@ -111,7 +111,9 @@ Error World::Impl::as_device_error(const std::exception& error) const {
 void World::Impl::check_can_step() const {
   if (!lost.empty()) throw Error(ErrorCode::device, lost + "; reset() opens it again");
   if (report.diverged)
-    throw Error(ErrorCode::diverged, report.message + "; reset() or load() goes back to a state that can be stepped, recover() to the one that was kept");
+    throw Error(
+        ErrorCode::diverged,
+        report.message + "; reset() or load() goes back to a state that can be stepped, recover() to the one that was kept");
 }
 
 void World::Impl::publish_clock() {
