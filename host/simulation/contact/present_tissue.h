@@ -37,8 +37,8 @@ class PresentTissue {
   /// at most `samples` points of the tool against the bodies, which detects tools that lie wholly inside or pass between
   /// surface points.
   [[nodiscard]] ToolOverlap overlap(const ToolForm& form, const Pose& pose, double time, std::size_t samples = 64) const;
-  /// Returns a point on the straight way between two poses where the tool is deeper in tissue than allowed at a start and deeper
-  /// than at `from`: the first contact point that it meets, or if there is none, the first of its own points.
+  /// Returns a point on the straight way between two poses where the tool is deeper in tissue than allowed at a start and
+  /// deeper than at `from`: the first contact point that it meets, or if there is none, the first of its own points.
   [[nodiscard]] ToolOverlap in_the_way(const ToolForm& form, const Pose& from, const Pose& to, double time) const;
 
   /// Throws Error (bad_input) if the tool starts deeper in a body than a quarter of a cell.
